@@ -92,8 +92,8 @@ _LOG = 1 << 12
 
 # entries of the state that the kernels share
 LENGTH, EVALUATED, ACCEPTED = 0, 1, 2
-# how far a pass over the candidates has come
-COUNT, NEXT, GAINED = 0, 1, 2
+# how far a pass over the candidates has come, and how many are positioned in a call
+COUNT, NEXT, GAINED, MOST = 0, 1, 2, 3
 
 
 @by_reference
@@ -251,14 +251,14 @@ def _try_operation(m, trial, rails, guard, record, key, operation, h):
 
 
 @kernel
-def coarsen_layout(m, trial, rails, guard, record, key, course, most, rng):
-    """Coarsen `m` in place by candidates in random order until none is accepted, or `most` were
-    positioned. trial, key: as in :func:`_try_operation`; course: where it goes on, kept from call
-    to call. Returns whether it came to an end.
+def coarsen_layout(m, trial, rails, guard, record, key, course, rng):
+    """Coarsen `m` in place by candidates in random order until none is accepted, or as many as
+    `course` has in MOST were positioned. trial, key: as in :func:`_try_operation`; course: where it
+    goes on, kept from call to call. Returns whether it came to an end.
     """
     found, at = course
     state = record.state
-    stop = state[EVALUATED] + most
+    stop = state[EVALUATED] + at[MOST]
     while True:
         if at[NEXT] >= at[COUNT]:
             if at[COUNT] >= 0 and not at[GAINED]:
@@ -518,11 +518,12 @@ class Coarsener:
         """
         guard = self.guard if aims is None else self.guard._replace(aims=aims)
         found = np.zeros((2 * len(layout.arrays.edge), 2), np.int64)
-        course = found, np.array([-1, 0, 0])
+        course = found, np.array([-1, 0, 0, 0])
         while stop is None or not stop():
+            course[1][MOST] = max(1, SLICE // int(layout.key[3]))
             ended = coarsen_layout(
                 layout.arrays, self._spare, self.rails, guard, layout.record, layout.key, course,
-                max(1, SLICE // int(layout.key[3])), self.rng,
+                self.rng,
             )  # fmt: skip
             if ended or not self._has_room(layout):
                 break
