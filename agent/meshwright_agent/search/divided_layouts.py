@@ -19,6 +19,8 @@ from meshwright_core.operations.catalogue import Operation
 
 FINEST = 1000
 """Elements that a layout may have once it is divided: positions for more take seconds."""
+FEW, AGAIN = 14, 3
+"""Inverted elements up to which the strips through them are divided once more, and how often."""
 
 WAYS, PROPOSALS = 30, 100_000
 """Ways down that are annealed from a state, and proposals of each."""
@@ -77,13 +79,16 @@ def collapse_chords(
     return done
 
 
-def divide_chords(mesh: HalfEdgeMesh) -> Operations:
-    """Cut every strip of a quad mesh in two, in place, but for those that close in a ring.
+def divide_chords(mesh: HalfEdgeMesh, through: np.ndarray | None = None) -> Operations:
+    """Cut strips of a quad mesh in two, in place, but for those that close in a ring.
 
+    through: ids of elements; by default all strips are cut, else those through these elements.
     Returns the operations.
     """
     crossing, ids = chords(mesh), mesh.element_ids()
-    _, first = np.unique(crossing.ravel(), return_index=True)
+    numbers, first = np.unique(crossing.ravel(), return_index=True)
+    if through is not None:
+        first = first[np.isin(numbers, crossing[np.isin(ids, through)])]
     done: Operations = []
     for place in first.tolist():
         # chord j of an element crosses its sides j and j + 2
@@ -104,8 +109,15 @@ def drawn_divided(
 ) -> tuple[Operations, bool]:
     """Divide the strips of a plane quad mesh, in place, and look for positions.
 
-    Returns the operations and whether nothing is inverted. A mesh that would have more than
-    :data:`FINEST` elements is drawn as it is.
+    Where few elements stay inverted the strips through them are divided once more: most of these
+    can then be drawn. Returns the operations and whether nothing is inverted. A mesh that would
+    have more than :data:`FINEST` elements is drawn as it is.
     """
     divisions = divide_chords(reached) if divisible(reached.n_elements) else []
-    return divisions, not len(draw(reached, stop, attempts))
+    inverted = draw(reached, stop, attempts)
+    for _ in range(AGAIN):
+        if not 0 < len(inverted) <= FEW or reached.n_elements > FINEST or stop():
+            break
+        divisions += divide_chords(reached, inverted)
+        inverted = draw(reached, stop, 1)
+    return divisions, not len(inverted)
