@@ -99,6 +99,7 @@ def built() -> str:
             npx,
             "--yes",
             "--prefer-offline",
+            "--update-notifier=false",  # npm tells of new versions of itself on stderr
             ESBUILD,
             "index.js",
             "--bundle",

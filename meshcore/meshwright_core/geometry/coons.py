@@ -30,6 +30,7 @@ from meshwright_core.core.compilation import kernel
 from meshwright_core.core.composite_curves import Curves
 from meshwright_core.core.references import by_reference
 from meshwright_core.geometry.edge_kernels import edge_offsets, place_on_edge
+from meshwright_core.geometry.vectors import determinant, inner
 
 NODES = 9
 """Places on a side where d and d' enter, at multiples of 1/8."""
@@ -175,16 +176,6 @@ def derivatives(curved, points, c, s, d, slope, p, q):
 
 
 @kernel
-def determinant(p, q, normal):
-    """p x q along `normal`, all (3,)."""
-    return (
-        normal[0] * (p[1] * q[2] - p[2] * q[1])
-        + normal[1] * (p[2] * q[0] - p[0] * q[2])
-        + normal[2] * (p[0] * q[1] - p[1] * q[0])
-    )
-
-
-@kernel
 def curved_shape(curved, points, c, normal):
     """Shape of curved element c from its worst sample: 1 for the ideal, 0 or less where folded.
 
@@ -198,10 +189,10 @@ def curved_shape(curved, points, c, normal):
     for s in range(len(curved.samples.nearest)):
         derivatives(curved, points, c, s, d, slope, p, q)
         det = determinant(p, q, normal)
-        squares = np.dot(p, p) + np.dot(q, q)
+        squares = inner(p, p) + inner(q, q)
         if k == 3:
             det *= np.sqrt(3.0)
-            squares = 2.0 * (squares - np.dot(p, q))
+            squares = 2.0 * (squares - inner(p, q))
         worst = min(worst, 2.0 * det / squares if squares > 0.0 else 0.0)
     return worst
 
@@ -224,8 +215,8 @@ def curved_corners(curved, points, reference):
         place_sides(curved, points, c, d, slope)
         for s in range(len(samples.nearest)):
             derivatives(curved, points, c, s, d, slope, p, q)
-            det, along = determinant(p, q, normal), np.dot(p, q)
-            pp, qq = np.dot(p, p), np.dot(q, q)
+            det, along = determinant(p, q, normal), inner(p, q)
+            pp, qq = inner(p, p), inner(q, q)
             corner = samples.nearest[s]
             if samples.at_corner[corner] == s:
                 # at the second and fourth corner of a quad one of p and q points to the corner
@@ -254,6 +245,6 @@ def at_corners(curved, points, normal):
         place_sides(curved, points, c, d, slope)
         for i in range(k):
             derivatives(curved, points, c, curved.samples.at_corner[i], d, slope, p, q)
-            lengths = np.sqrt(np.dot(p, p) * np.dot(q, q))
+            lengths = np.sqrt(inner(p, p) * inner(q, q))
             sines[c, i] = determinant(p, q, normal) / lengths if lengths > 0.0 else 0.0
     return sines

@@ -20,10 +20,10 @@ from meshwright_core.geometry.coons import (
     CurvedElements,
     Samples,
     derivatives,
-    determinant,
     place_sides,
 )
 from meshwright_core.geometry.turning import BENDS, turning_between
+from meshwright_core.geometry.vectors import determinant, inner
 
 MOST_TURN = np.radians(300.0)
 """Radians that one edge may turn: the samples of an element see no more."""
@@ -125,7 +125,7 @@ def element_sine(m, turning, gauge, e):
     worst = 1.0
     for s in range(len(gauge.samples.nearest)):
         derivatives(curved, gauge.points, 0, s, gauge.d, gauge.slope, p, q)
-        first, second = np.sqrt(np.dot(p, p)), np.sqrt(np.dot(q, q))
+        first, second = np.sqrt(inner(p, p)), np.sqrt(inner(q, q))
         lengths = first * second
         sine = determinant(p, q, normal) / lengths if lengths > 0.0 else 0.0
         worst = min(worst, thinness(first, second) * sine)

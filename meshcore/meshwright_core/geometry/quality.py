@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from meshwright_core.core.compilation import kernel
-from meshwright_core.geometry.coons import curved_corners, determinant
+from meshwright_core.geometry.coons import curved_corners
 from meshwright_core.geometry.curved_elements import curved_elements
 from meshwright_core.geometry.planes import plane_normal, unit, vector_areas
+from meshwright_core.geometry.vectors import determinant
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh

@@ -7,6 +7,7 @@ import numpy as np
 from meshwright_core.core.compilation import kernel
 from meshwright_core.core.composite_curves import Curves, curve_length, place_in_span
 from meshwright_core.geometry.turning import Turning
+from meshwright_core.geometry.vectors import inner
 
 SHARP = 1e-9
 """Radians of turning at a joint above which it is a kink."""
@@ -19,7 +20,7 @@ def _turns_to_left(curves, spans, previous, normal):
     for i in range(len(spans)):
         place_in_span(curves, previous[i], 1.0, point, come)
         place_in_span(curves, spans[i], 0.0, point, go)
-        length = np.sqrt(np.dot(come, come) * np.dot(go, go))
+        length = np.sqrt(inner(come, come) * inner(go, go))
         across = 0.0
         for c in range(3):
             d, e = (c + 1) % 3, (c + 2) % 3

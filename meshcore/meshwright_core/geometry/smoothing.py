@@ -21,6 +21,7 @@ from meshwright_core.geometry.quality import TOLERANCE
 from meshwright_core.geometry.seats import place_seat
 from meshwright_core.geometry.unfixable import fixable
 from meshwright_core.geometry.untangling import ALL, untangle_from_sides, untangle_part
+from meshwright_core.geometry.vectors import inner
 
 if TYPE_CHECKING:
     from meshwright_core.mesh import HalfEdgeMesh
@@ -125,7 +126,7 @@ def move_to_means(points, stars, order, seats, curves, guarded):
         shift = 0.0
         if slides:
             place_seat(curves, seats, v, points[v], tangent)
-            shift = np.dot(tangent, mean) / np.dot(tangent, tangent)
+            shift = inner(tangent, mean) / inner(tangent, tangent)
             low, high = seats.low[v], seats.high[v]
             if seats.before[v] >= 0:
                 low += seats.parameter[seats.before[v]]
@@ -134,9 +135,9 @@ def move_to_means(points, stars, order, seats, curves, guarded):
             margin = GAP * (high - low)
             shift = min(max(start + shift, low + margin), high - margin) - start
         else:
-            square = np.dot(normal, normal)
+            square = inner(normal, normal)
             if square > 0.0:
-                along = np.dot(mean, normal) / square
+                along = inner(mean, normal) / square
                 for c in range(3):
                     mean[c] -= along * normal[c]
         worst = np.inf

@@ -225,6 +225,35 @@ def names_of(mesh: HalfEdgeMesh, number: Ints, kind: str) -> Names:
     )
 
 
+class RegionGroups(NamedTuple):
+    """The regions of a mesh that is written, told apart by their number and their name."""
+
+    rows: list[int]
+    """The row of each region's name, -1 for none."""
+    keys: list[str]
+    """The name of each, or "region=N"."""
+    place: Ints
+    """(m,) which of them each element is in."""
+    tags: dict[str, int]
+    """A number for each key, as :func:`tags_of` gives them."""
+
+    def numbers(self) -> Ints:
+        """(m,) the number of the region of each element."""
+        return np.array([self.tags[key] for key in self.keys], np.int64)[self.place]
+
+
+def region_groups(content: Content, kind: str, count: int) -> RegionGroups:
+    """The regions of the `count` elements of this kind."""
+    names = content.names or Names()
+    number = (content.regions or {}).get(kind)
+    number = np.zeros(count, np.int64) if number is None else np.asarray(number)
+    row = names.elements.get(kind, np.full(count, -1, np.int64))
+    pairs, place = unique_pairs(number, row)
+    keys = [names.regions[int(one)] if one >= 0 else f"region={int(n) + 1}" for n, one in pairs]
+    tags = tags_of(list(dict.fromkeys(keys)), 2, names.tags)
+    return RegionGroups([int(one) for _, one in pairs], keys, place, tags)
+
+
 def group_rows(names: Names, kind: str) -> dict[str, Ints]:
     """The elements in each group of regions, in the order of the names."""
     row = names.elements.get(kind, np.zeros(0, np.int64))

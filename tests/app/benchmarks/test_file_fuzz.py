@@ -5,7 +5,7 @@ import pytest
 
 from meshwright.benchmarks import file_fuzz
 from meshwright.benchmarks.hostile_files import Kind
-from meshwright_core.io.formats import FORMATS, SHAPES
+from meshwright_core.io.formats import FORMATS, SHAPES, missing_package
 
 OTHERS = (".meshwright", ".safetensors", "level.json", "airfoil.dat")
 
@@ -23,7 +23,9 @@ def test_all_kinds_have_sources(kinds):
 @pytest.mark.parametrize("ending", [*FORMATS, *SHAPES, *OTHERS])
 def test_mutations_cause_no_fault(ending, kinds, tmp_path):
     if ending not in kinds:
-        pytest.skip("needs a package that is not installed")
+        package = missing_package(FORMATS[ending])
+        assert package
+        pytest.skip(f"needs {package}, a package that is not installed")
     kind = kinds[ending]
     path = tmp_path / f"a{ending}"
     for whole in kind.sources:

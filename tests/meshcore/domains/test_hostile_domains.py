@@ -55,6 +55,7 @@ def test_triangle_runs_in_a_process_of_its_own_where_points_nearly_coincide(monk
 
     monkeypatch.setattr(triangle_process, "triangulate", counted)
     meshing.mesh_domain(Domain(SQUARE), "tri")
+    meshing.mesh_domain(comb(1200, 0.1), "quad")  # many points, but apart
     assert not calls
     notch = [[0, 0], [1, 0], [1, 1], [0.5 + 1e-9, 1], [0.5, 0.1], [0.5 - 1e-9, 1], [0, 1]]
     meshing.mesh_domain(Domain(notch), "quad").validate()

@@ -64,6 +64,9 @@ from meshwright.puzzles.level import Level
 
 WORDS_FROM = 1040
 """Width of the window in pixels from which the toolbar has words beside icons."""
+FIRST_FRAME = 50
+"""Milliseconds after which the first frame is on its way: what prepares the kernels would delay it.
+"""
 
 
 class MainWindow(QMainWindow):
@@ -413,7 +416,7 @@ class MainWindow(QMainWindow):
         self.canvas.focus()
         self.opened.emit()
         if not self.readiness.editing:
-            QTimer.singleShot(0, self.warmup.start)
+            QTimer.singleShot(FIRST_FRAME, self.warmup.start)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Escape gives the keyboard focus to the canvas; other keys that nothing has used are

@@ -158,8 +158,12 @@ class CutElements:
         tree = shapely.STRtree(shapely.linestrings(shapes))
         low = np.zeros(len(rows))
         high = np.full(len(rows), float(np.ptp(self.points, axis=0).max()))
-        # points of sides that have been found too near once rule out most of the larger circles
+        # points of sides rule out most of the larger circles: the corners of the triangle first,
+        # then those of a side that has been found too near once
+        on_sides = triangles[rows, :, None] < len(self.edges.curve)
+        corner_points = np.where(on_sides, self.points[triangles[rows]], np.inf)
         known = np.full((len(rows), len(SAMPLES), 2), np.inf)
+        known = np.concatenate([corner_points, known], axis=1)
         for _ in range(_HALVINGS):
             check_time()
             middle = 0.5 * (low + high)
@@ -171,7 +175,7 @@ class CutElements:
             (which, side), distance = tree.query_nearest(
                 shapely.points(spots[open_]), return_distance=True, all_matches=False
             )
-            known[open_[which]] = shapes[side]
+            known[open_[which], 3:] = shapes[side]
             clear[open_[which]] = distance >= reach[open_[which]]
             low, high = np.where(clear, middle, low), np.where(clear, high, middle)
         found = np.zeros((len(triangles), 2))

@@ -23,7 +23,7 @@ MAX_TRIANGLES = 4_000_000
 _ROUNDS = 200
 _FIRST_MARKER = 2
 """Triangle gives 0 and 1 a meaning of their own."""
-_FEW, _NEAR = 3000, 1e-5
+_FEW, _NEAR = 20_000, 1e-5
 """Points, and their distance from each other and from sides as a share of the size: with more, or
 less, Triangle runs in a process of its own."""
 _PER_SECOND, _LEAST = 40_000, 1000

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.names import numbered
 from meshwright_core.io.content import Content
-from meshwright_core.io.named_groups import group_edges, group_rows, tags_of, unique_pairs
+from meshwright_core.io.named_groups import group_edges, group_rows, region_groups, tags_of
 from meshwright_core.io.writers import lines as form
 
 _PLAIN = ":=&()[]{}<>,;.+*/!?@#$"
@@ -81,15 +81,10 @@ def referenced_cells(
     """
     kind, elements = form.block(content)
     names = form.names(content)
-    row = names.elements.get(kind, np.full(len(elements), -1, np.int64))
-    number = (content.regions or {}).get(kind)
-    number = np.zeros(len(elements), np.int64) if number is None else np.asarray(number)
-    pairs, place = unique_pairs(number, row)
-    keys = [names.regions[int(one)] if one >= 0 else f"region={int(n) + 1}" for n, one in pairs]
-    plain = len(keys) == 1 and not names.regions
-    tags = tags_of(list(dict.fromkeys(keys)), 2, names.tags)
-    found = np.array([0 if plain else tags[key] for key in keys], np.int32)[place]
-    cells, data = {kind: elements}, [found]
+    groups = region_groups(content, kind, len(elements))
+    plain = len(groups.keys) == 1 and not names.regions
+    number = np.zeros(len(elements), np.int64) if plain else groups.numbers()
+    cells, data = {kind: elements}, [number.astype(np.int32)]
     if edges and len(names.edges):
         side = tags_of(list(names.sides), 1, names.tags)
         cells["line"] = names.edges

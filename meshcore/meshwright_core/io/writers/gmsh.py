@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from meshwright_core.core.names import groups
 from meshwright_core.io.content import Content
-from meshwright_core.io.named_groups import group_edges, group_rows, tags_of, unique_pairs
+from meshwright_core.io.named_groups import group_edges, group_rows, region_groups, tags_of
 from meshwright_core.io.writers import lines as form
 
 _CODES = {"line": 1, "triangle": 2, "quad": 3}
@@ -25,21 +25,19 @@ class _Writer:
     def __init__(self, content: Content) -> None:
         self.content, self.names = content, form.names(content)
         self.kind, self.elements = form.block(content)
-        numbers = (content.regions or {}).get(self.kind)
-        self.numbers = np.zeros(len(self.elements), np.int64) if numbers is None else numbers
         tags = self.names.tags
         self.surfaces = tags_of(list(group_rows(self.names, self.kind)), 2, tags)
         self.curves = tags_of(list(group_edges(self.names)), 1, tags)
-        row = self.names.elements.get(self.kind, np.full(len(self.elements), -1, np.int64))
         # one entity for each region: by its number in the mesh and its name
-        self.pairs, self.entity = unique_pairs(self.numbers, row)
-        self.physical = [self._physical(int(one)) for _, one in self.pairs]
+        regions = region_groups(content, self.kind, len(self.elements))
+        self.entity, self.alone = regions.place, len(regions.rows) == 1
+        self.physical = [self._physical(row) for row in regions.rows]
 
     def _physical(self, row: int) -> list[int]:
         """The physical groups of a region by the row of its name, -1 for none."""
         if row >= 0:
             return [self.surfaces[group] for group in groups(self.names.regions[row])]
-        if len(self.pairs) == 1:
+        if self.alone:
             return []
         free = max([0, *self.surfaces.values()]) + 1
         self.surfaces[str(free)] = free

@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwright_core.core.names import numbered
 from meshwright_core.io.content import Content
-from meshwright_core.io.named_groups import group_edges, group_rows, tags_of, unique_pairs
+from meshwright_core.io.named_groups import group_edges, group_rows, region_groups
 from meshwright_core.io.writers import lines as form
 
 _SHELL = {"triangle": 91, "quad": 94}
@@ -27,7 +27,7 @@ def write(content: Content) -> str:
     edges, place = np.unique(np.sort(names.edges, axis=1), axis=0, return_inverse=True)
     if len(edges):
         edges = names.edges[np.unique(place.ravel(), return_index=True)[1]]
-    owner = _properties(content, kind, len(elements))
+    owner = region_groups(content, kind, len(elements)).numbers()
     for i, nodes in enumerate((edges + 1).tolist(), start=1):
         lines += [_row(i, _BEAM, 1, 1, 7, 2), _row(0, 0, 0), _row(*nodes)]
     first = len(edges) + 1
@@ -50,18 +50,6 @@ def write(content: Content) -> str:
     if members:
         lines += ["    -1", "  2467", *_groups(members), "    -1"]
     return form.text(lines)
-
-
-def _properties(content: Content, kind: str, count: int) -> np.ndarray:
-    """The number of the property of each element: of its region."""
-    names = form.names(content)
-    number = (content.regions or {}).get(kind)
-    number = np.zeros(count, np.int64) if number is None else np.asarray(number)
-    row = names.elements.get(kind, np.full(count, -1, np.int64))
-    pairs, place = unique_pairs(number, row)
-    keys = [names.regions[int(one)] if one >= 0 else f"region={int(n) + 1}" for n, one in pairs]
-    tags = tags_of(list(dict.fromkeys(keys)), 2, names.tags)
-    return np.array([tags[key] for key in keys], np.int64)[place]
 
 
 def _groups(members: dict[str, np.ndarray]) -> list[str]:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from meshwright_core.errors import MeshError
 from meshwright_core.io.content import Content
-from meshwright_core.io.named_groups import tags_of, unique_pairs
+from meshwright_core.io.named_groups import region_groups
 from meshwright_core.io.writers import lines as form
 
 
@@ -32,21 +30,14 @@ def write(content: Content) -> str:
 
 def _properties(content: Content, kind: str, count: int) -> tuple[list[int], list[str]]:
     """The property of each element, and the comments that name properties."""
-    names = form.names(content)
-    numbers = (content.regions or {}).get(kind)
-    numbers = np.zeros(count, np.int64) if numbers is None else np.asarray(numbers)
-    row = names.elements.get(kind, np.full(count, -1, np.int64))
-    pairs, place = unique_pairs(numbers, row)
-    bare = [int(number) for number, one in pairs if one < 0]
-    keys = [names.regions[int(one)] if one >= 0 else f"region={int(n) + 1}" for n, one in pairs]
-    tags = tags_of(list(dict.fromkeys(keys)), 2, names.tags)
-    owners = np.array([tags[key] for key in keys])[place]
+    found = region_groups(content, kind, count)
+    bare = any(row < 0 for row in found.rows)
     comments = [
         f'$HMNAME PROP          {tag:>8}"{key.replace(chr(34), chr(39))}"'
-        for key, tag in tags.items()
+        for key, tag in found.tags.items()
         if not (key.startswith("region=") and bare) and key != f"property={tag}"
     ]
-    return owners.tolist(), comments
+    return found.numbers().tolist(), comments
 
 
 def _in_16(value: float) -> str:
