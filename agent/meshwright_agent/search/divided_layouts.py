@@ -19,8 +19,8 @@ from meshwright_core.operations.catalogue import Operation
 
 FINEST = 1000
 """Elements that a layout may have once it is divided: positions for more take seconds."""
-FEW, AGAIN = 14, 3
-"""Inverted elements up to which the strips through them are divided once more, and how often."""
+FEW = 14
+"""Inverted elements up to which the strips through them are divided once more."""
 
 WAYS, PROPOSALS = 30, 100_000
 """Ways down that are annealed from a state, and proposals of each."""
@@ -109,15 +109,13 @@ def drawn_divided(
 ) -> tuple[Operations, bool]:
     """Divide the strips of a plane quad mesh, in place, and look for positions.
 
-    Where few elements stay inverted the strips through them are divided once more: most of these
-    can then be drawn. Returns the operations and whether nothing is inverted. A mesh that would
-    have more than :data:`FINEST` elements is drawn as it is.
+    Where few elements stay inverted the strips through them are divided once more, after which more
+    than half of these can be drawn. A mesh that would have more than :data:`FINEST` elements at
+    first is drawn as it is. Returns the operations and whether nothing is inverted.
     """
     divisions = divide_chords(reached) if divisible(reached.n_elements) else []
     inverted = draw(reached, stop, attempts)
-    for _ in range(AGAIN):
-        if not 0 < len(inverted) <= FEW or reached.n_elements > FINEST or stop():
-            break
+    if 0 < len(inverted) <= FEW and reached.n_elements <= FINEST and not stop():
         divisions += divide_chords(reached, inverted)
         inverted = draw(reached, stop, 1)
     return divisions, not len(inverted)

@@ -3,9 +3,10 @@ of them.
 
 Guarded rollouts (:mod:`meshwright_agent.search.guarded_rollouts`) are cheap, and most end a little
 above s*, each in another state. With all strips cut in two there is room for more operations, so
-that a rollout from there often goes on. A leap (:mod:`meshwright_agent.search.leaps`) or a way
-down by annealing often leads on; so does a free rollout from the start, though little of what it
-reaches can be drawn before its strips are divided
+that a rollout from there often goes on. Where s* is hard to reach, most often a leap
+(:mod:`meshwright_agent.search.leaps`) leads there, from some states in every second try and from
+others never, so that each new state is tried soon. Sometimes only a way down by annealing does, or
+a free rollout, though little of what it reaches can be drawn before its strips are divided
 (:mod:`meshwright_agent.search.divided_layouts`). What works differs from part to part, so all of it
 takes turns.
 """
@@ -46,25 +47,29 @@ from meshwright_core.operations.catalogue import NAMES
 TOGETHER, ELEMENTS_EACH = 2, 200
 """The most guarded rollouts side by side, and elements of all of them together: on a large mesh one
 comes further in the same time."""
-ROUNDS = 6
-"""Guarded rollouts from the start in each turn."""
+ROUNDS, ROUNDS_LATER = 6, 4
+"""Guarded rollouts from the start in the first turn, and in each later one."""
 STALLED_LATER = 80
 """Decisions without a lower s after which a rollout ends from the second turn on: where s* is hard
 to reach, more of the long ones do."""
-CONTINUED = 1, 2
-"""Guarded rollouts from a state as it is, and divided: from most states none leads on, from some
-nearly all do."""
-CONTINUED_STATES = 2
-"""States from which these are made in each turn, as long as none leads on."""
-KEPT = 12
+CONTINUED_STATES = 4
+"""States that are gone on from in each turn, as long as none leads on."""
+SMALL, GROWTH = 100, 1.3
+"""Elements of a state below which the first leap from it is made with its strips cut in two, the
+second without, and so on; from a larger one it is the other way round. By how much a leap may
+multiply them."""
+KEPT, ABOVE = 40, 4
 """States that are kept, of the lowest s and up to `ABOVE` more."""
-ABOVE = 4
+GATHERED = 12
+"""States of the lowest s up to which further ones are looked for."""
 FREE_WORK, MOST_FREE = 1500, 16
 """Free rollouts from a state in each turn, in its elements and in number."""
 COARSE = 120
 """Elements down to which these are coarsened first."""
 FREE_DRAWN = ((4, 1), (1, 2))
 """How many of their results are given positions, with how many attempts; then again."""
+ANNEALED_EVERY = 2
+"""Turns in which a state is annealed once."""
 LARGEST_ANNEALED = 250
 """Elements up to which a state is annealed."""
 ANNEALED_DRAWN = 6
@@ -77,8 +82,8 @@ class GuardedDescent:
     """A descent to s* through states without inverted elements.
 
     Each turn makes guarded rollouts from the start, some of them with its strips cut in two; goes
-    on from the states of low s that were tried least by guarded rollouts, from the state as it is
-    and divided, and by leaps; anneals; and makes free rollouts from the best state or the start.
+    on from the states of low s that were tried least, by leaps, and at first by guarded rollouts
+    too; anneals at times; and makes free rollouts from a state of the lowest s and from the start.
 
     Args:
         mesh: the start, without inverted elements; it is not changed.
@@ -129,20 +134,27 @@ class GuardedDescent:
         turn = 0
         while not over() and granted(1) > 0:
             self._stalled = STALLED if turn == 0 else STALLED_LATER
-            turn += 1
-            for i in range(ROUNDS // together):
+            rounds = (ROUNDS if turn == 0 else ROUNDS_LATER) // together
+            for i in range(rounds):
                 if not over() and (count := granted(together)) > 0:
-                    self._round(self._start, count, stop, divide=i == 1 and divides)
+                    divide = divides and i == 1 and turn % 2 == 0
+                    self._round(self._start, count, stop, divide)
+            turn += 1
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
                 self._go_on(granted, stop)
                 before, tried = self.score, 0 if self.score < before else tried + 1
-            while self.states and not over() and self._anneal(stop):
-                pass
-            begin = self.states[0] if self.states and turn % 2 else self._start
-            free = max(2, min(MOST_FREE, FREE_WORK // begin.elements))
-            if not over() and (count := granted(free)) > 0:
-                self._free(begin, count, stop)
+            if self.states and turn % ANNEALED_EVERY == 0 and not over():
+                self._anneal(stop)
+            for begin in [*self._any_lowest(), self._start]:
+                free = max(2, min(MOST_FREE, FREE_WORK // begin.elements))
+                if not over() and (count := granted(free)) > 0:
+                    self._free(begin, count, stop)
+
+    def _any_lowest(self) -> list[DrawnState]:
+        """One of the states of the lowest s, if there is any."""
+        lowest = self.lowest
+        return [lowest[int(self._rng.integers(len(lowest)))]] if lowest else []
 
     def _note(self, state: DrawnState) -> None:
         """Add a state to those found."""
@@ -174,20 +186,19 @@ class GuardedDescent:
         return lower
 
     def _go_on(self, granted: Callable[[int], int], stop: Callable[[], bool]) -> None:
-        """Guarded rollouts from a state, then from it divided, then a leap, until one leads on."""
+        """A leap from a state, and at the first try guarded rollouts from it as it is and divided,
+        until one of them leads on.
+        """
         state = self._least_tried(self.states)
-        before = self.score
-        ways = CONTINUED if divisible(state.elements) else CONTINUED[:1]
-        for divide, rollouts in enumerate(ways):
-            for _ in range(granted(rollouts)):
-                if self.score == before and not stop():
-                    self._round(state, 1, stop, bool(divide))
-        if self.score == before and not stop():
-            self._leap(state, stop)
+        before, divides = self.score, divisible(state.elements)
+        self._leap(state, stop, divides and (state.tries % 2 == 1) == (state.elements < SMALL))
+        for divide in (False, True)[: 1 + divides] if state.tries == 1 else ():
+            if self.score == before and granted(1) > 0 and not stop():
+                self._round(state, 1, stop, divide)
 
     def gather(self, stop: Callable[[], bool]) -> None:
         """Guarded rollouts from the start until `stop`: further states of the lowest s."""
-        while self._start.score > self.score and len(self.lowest) < KEPT and not stop():
+        while self._start.score > self.score and len(self.lowest) < GATHERED and not stop():
             self._round(self._start, 1, stop)
 
     def another(self, stop: Callable[[], bool]) -> DrawnState | None:
@@ -198,19 +209,21 @@ class GuardedDescent:
     @staticmethod
     def _least_tried(states: list[DrawnState]) -> DrawnState:
         """The state from which something was tried least often, which is counted; a state of an s
-        higher by two counts as tried once more.
+        higher by two counts as tried once more. Of several the largest one has the most room.
         """
-        state = min(states, key=lambda one: (one.score // 2 + one.tries, one.rank))
+        state = min(states, key=lambda one: (one.score // 2 + one.tries, -one.elements))
         state.tries += 1
         return state
 
-    def _leap(self, state: DrawnState, stop: Callable[[], bool]) -> None:
-        """Leap from a state to lower s."""
+    def _leap(self, state: DrawnState, stop: Callable[[], bool], divide: bool) -> None:
+        """Leap from a state, or from what its strips cut in two make of it, to lower s."""
         mesh = state.mesh(self._mesh)
-        found = leap(mesh, self._policy, self._rng, stop, self._ceiling, divide=True)
+        before = state.operations + (divide_chords(mesh) if divide else [])
+        ceiling = max(self._ceiling, int(GROWTH * mesh.n_elements))
+        found = leap(mesh, self._policy, self._rng, stop, ceiling, divide=True)
         if found is not None:
             operations, arrays = found
-            self._note(self._thinned(DrawnState.of(state.operations + operations, arrays), stop))
+            self._note(self._thinned(DrawnState.of(before + operations, arrays), stop))
 
     def _anneal(self, stop: Callable[[], bool]) -> bool:
         """Anneal from a state, to s* or else to any lower s, and divide what that leads to; returns

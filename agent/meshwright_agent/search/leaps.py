@@ -11,6 +11,7 @@ taken, or the first one that can be drawn when it is divided
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import islice
 
 import numpy as np
 import torch
@@ -23,8 +24,9 @@ from meshwright_agent.search.annealing import Operations, with_room
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.divided_layouts import drawn_divided
 from meshwright_core.core.arrays import MeshArrays, copied
-from meshwright_core.geometry.layout_positions import rails_of
+from meshwright_core.geometry.layout_positions import layout_bound, rails_of
 from meshwright_core.geometry.local_positions import local_effort, settle
+from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES, Operation
 
@@ -36,6 +38,8 @@ TRIED = 5
 """Leaps that are positioned."""
 DIVIDED = 3
 """Leaps that are divided where none can be drawn as it is."""
+LEAST = 0.1
+"""Sine of the worst corner that the degrees of a leap must permit for it to be divided."""
 RINGS = 3
 """Rings of elements around what has changed whose vertices move too."""
 
@@ -59,7 +63,7 @@ def leap(
     if ceiling is None:
         ceiling = policy.task.bounds(mesh.n_elements)[1]
     before = with_room(mesh, ceiling)
-    rails = rails_of(mesh, len(before.vertex))
+    rails, angle = rails_of(mesh, len(before.vertex)), corner_angles(mesh)
     local = local_effort(rings=RINGS, thorough=False)
     active = np.zeros(len(before.points), np.bool_)
     cleaned, touched = np.zeros(MOST_CLEANUPS, np.int64), np.zeros(16, np.int64)
@@ -76,8 +80,11 @@ def leap(
         if settle(before, after, rails, local, active) > 0.0:
             return operations, after
         found.append(operations)
-    for operations in found[: DIVIDED if divide else 0]:
-        reached = replayed(mesh, operations)
+    if not divide:
+        return None
+    results = ((operations, replayed(mesh, operations)) for operations in found)
+    drawable = (pair for pair in results if layout_bound(pair[1].arrays, angle) > LEAST)
+    for operations, reached in islice(drawable, DIVIDED):
         divisions, drawn = drawn_divided(reached, stop, 1)
         if drawn:
             return operations + divisions, reached.arrays

@@ -6,8 +6,10 @@ import numpy as np
 from tests.helpers import curved_meshes
 from tests.helpers.tiny_meshes import grid
 
+from meshwright_agent.search import divided_layouts
 from meshwright_agent.search.coarsening import replayed
 from meshwright_agent.search.divided_layouts import (
+    FEW,
     LONGEST,
     collapse_chords,
     divide_chords,
@@ -31,6 +33,29 @@ def test_every_strip_is_divided_once():
     assert len(operations) == 5 and mesh.n_elements == 24
     assert replayed(start, operations).n_elements == 24
     mesh.validate()
+
+
+def test_only_the_strips_through_some_elements_are_divided():
+    mesh = grid(3, 2)
+    operations = divide_chords(mesh, np.array([4]))
+    assert len(operations) == 2 and mesh.n_elements == 4 * 3
+    mesh.validate()
+
+
+def test_strips_through_what_stays_inverted_are_divided_once_more(monkeypatch):
+    left = [np.array([0]), np.array([], int)]
+    monkeypatch.setattr(divided_layouts, "draw", lambda *_: left.pop(0))
+    mesh = grid(3, 2)
+    operations, drawn = drawn_divided(mesh, never, 1)
+    assert drawn and not left
+    assert len(operations) == 5 + 2 and mesh.n_elements == 7 * 5
+
+
+def test_strips_through_many_inverted_elements_stay(monkeypatch):
+    monkeypatch.setattr(divided_layouts, "draw", lambda *_: np.arange(FEW + 1))
+    mesh = grid(3, 2)
+    operations, drawn = drawn_divided(mesh, never, 1)
+    assert not drawn and len(operations) == 5
 
 
 def test_strips_are_collapsed_down_to_a_size():
