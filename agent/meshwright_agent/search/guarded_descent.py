@@ -142,7 +142,7 @@ class GuardedDescent:
             turn += 1
             before, tried = self.score, 0
             while self.states and tried < CONTINUED_STATES and not over():
-                self._go_on(granted, stop)
+                self._go_on(self._least_tried(self.states), granted, stop)
                 before, tried = self.score, 0 if self.score < before else tried + 1
             if self.states and turn % ANNEALED_EVERY == 0 and not over():
                 self._anneal(stop)
@@ -185,21 +185,27 @@ class GuardedDescent:
             self._note(state)
         return lower
 
-    def _go_on(self, granted: Callable[[int], int], stop: Callable[[], bool]) -> None:
+    def _go_on(
+        self, state: DrawnState, granted: Callable[[int], int], stop: Callable[[], bool]
+    ) -> None:
         """A leap from a state, and at the first try guarded rollouts from it as it is and divided,
         until one of them leads on.
         """
-        state = self._least_tried(self.states)
-        before, divides = self.score, divisible(state.elements)
+        known, divides = len(self.states), divisible(state.elements)
         self._leap(state, stop, divides and (state.tries % 2 == 1) == (state.elements < SMALL))
         for divide in (False, True)[: 1 + divides] if state.tries == 1 else ():
-            if self.score == before and granted(1) > 0 and not stop():
+            if len(self.states) == known and granted(1) > 0 and not stop():
                 self._round(state, 1, stop, divide)
 
     def gather(self, stop: Callable[[], bool]) -> None:
-        """Guarded rollouts from the start until `stop`: further states of the lowest s."""
+        """Look for further states of the lowest s until `stop`, by guarded rollouts from the start
+        and by what leads on from states above.
+        """
         while self._start.score > self.score and len(self.lowest) < GATHERED and not stop():
             self._round(self._start, 1, stop)
+            above = [state for state in self.states if state.score > self.score]
+            if above and not stop():
+                self._go_on(self._least_tried(above), lambda wanted: wanted, stop)
 
     def another(self, stop: Callable[[], bool]) -> DrawnState | None:
         """A further state of the lowest s, if a guarded rollout from the start reaches one."""

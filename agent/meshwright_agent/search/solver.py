@@ -77,8 +77,10 @@ DESCENT = 0.9
 DRAWN, ADDED = 2, 0.25
 """States found by guarded rollouts whose layouts are searched, at least; more are added up to this
 share of the time."""
-GATHERED = 0.15
-"""Share of the time in which more of them are looked for once there is one at s*."""
+GATHERED, GATHERED_LARGE = 0.15, 0.4
+"""Share of the time in which more of them are looked for once there is one at s*; and if none has
+at most `COARSE_ENOUGH` elements."""
+COARSE_ENOUGH = 200
 PATCHING, SMOOTHING = 0.75, 0.9
 """Shares of the time after which no more patches are improved, and none smoothed, on a large
 mesh: what follows takes the longer the more was done."""
@@ -194,7 +196,7 @@ def _search_layouts(
         share = None if search.wanted is None else search.book(search.wanted) / workers
         side_by_side(len(descents), lambda i: _descend(search, descents[i], share))
         if timed and any(descent.score == mesh.optimum for descent in descents):
-            side_by_side(len(descents), lambda i: descents[i].gather(lambda: search.over(GATHERED)))
+            side_by_side(len(descents), lambda i: _gather(search, descents[i]))
     drawn = min((descent.score for descent in descents), default=mesh.score)
     if search.score > mesh.optimum and drawn == mesh.score:
         search.look(workers, share=OPENING)
@@ -305,6 +307,18 @@ def _descend(search: _Search, descent: GuardedDescent, most: float | None) -> No
     before = descent.rollouts
     descent.run(lambda: search.over(DESCENT), None if most is None else math.ceil(most))
     search.count(descent.rollouts - before)
+
+
+def _gather(search: _Search, descent: GuardedDescent) -> None:
+    """Look for further states of the lowest s: longer where all are large, since such layouts stay
+    large and take long to improve.
+    """
+
+    def enough() -> bool:
+        small = descent.lowest[0].elements <= COARSE_ENOUGH
+        return search.over(GATHERED if small else GATHERED_LARGE)
+
+    descent.gather(enough)
 
 
 def _add_coarsest(
