@@ -17,7 +17,7 @@ from contextlib import contextmanager
 
 from meshwright_core.core.compilation import cache_folder, entry_points_on_disk
 
-ENTRY_POINTS = 75
+ENTRY_POINTS = 76
 """Kernels of both packages that :func:`warm` stores on disk, for progress messages; tested."""
 
 _MARK = "warm"

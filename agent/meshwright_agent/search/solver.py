@@ -45,7 +45,9 @@ from meshwright_agent.search.solution import Solution, judged
 from meshwright_core.domains.gallery import shape
 from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 from meshwright_core.geometry import smoothing
+from meshwright_core.geometry.layout_positions import layout_bound
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
+from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.geometry.turning import has_bends
 from meshwright_core.mesh import HalfEdgeMesh
 
@@ -480,6 +482,7 @@ def _warm_up(policy: Policy) -> None:
 def _warm_up_curves() -> None:
     """Kick and judge layouts whose sides bend; all else is the same as for straight sides."""
     plate = mesh_domain(shape("plate-with-round-hole"), "quad")
+    layout_bound(plate.arrays, corner_angles(plate))
     seeker = LayoutSearch(plate, Preference())
     seeker.add([], True, lambda: False)
     seeker.run(lambda: False, 16)
