@@ -13,12 +13,15 @@ import numpy as np
 
 from meshwright_agent.search.annealing import Annealer, Operations
 from meshwright_core.analysis.element_division import chords
+from meshwright_core.geometry.layout_positions import layout_bound
 from meshwright_core.geometry.smoothing import draw
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import Operation
 
 FINEST = 1000
 """Elements that a layout may have once it is divided: positions for more take seconds."""
+LEAST_BOUND = 0.1
+"""Sine of the worst corner that the degrees of a layout must permit for it to be drawn."""
 FEW = 14
 """Inverted elements up to which the strips through them are divided once more."""
 
@@ -97,6 +100,15 @@ def divide_chords(mesh: HalfEdgeMesh, through: np.ndarray | None = None) -> Oper
             mesh.apply(Operation.DIVIDE_CHORD, h)
             done.append((Operation.DIVIDE_CHORD, h))
     return done
+
+
+def drawable(mesh: HalfEdgeMesh, angle: np.ndarray) -> bool:
+    """Whether the degrees of a quad mesh permit corners that are worth looking for positions.
+
+    angle: radians of the corners of the boundary by vertex, see
+    :func:`meshwright_core.geometry.shape_bound.corner_angles`; operations add no corner.
+    """
+    return bool(layout_bound(mesh.arrays, angle) > LEAST_BOUND)
 
 
 def divisible(elements: int) -> bool:

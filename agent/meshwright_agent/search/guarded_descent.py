@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -25,12 +26,12 @@ from meshwright_agent.search.divided_layouts import (
     collapse_chords,
     divide_chords,
     divisible,
+    drawable,
     drawn_divided,
     ways_down,
 )
 from meshwright_agent.search.guarded_rollouts import (
     STALLED,
-    THIN_LEAST,
     DrawnState,
     GuardedRollouts,
     thin_out,
@@ -39,7 +40,7 @@ from meshwright_agent.search.guarded_rollouts import (
 from meshwright_agent.search.leaps import leap
 from meshwright_agent.search.search_worker import RolloutBatch, Worker
 from meshwright_core.core.arrays import JOURNALLING, copied
-from meshwright_core.geometry.layout_positions import layout_bound, rails_of
+from meshwright_core.geometry.layout_positions import rails_of
 from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.mesh import HalfEdgeMesh
 from meshwright_core.operations.catalogue import NAMES
@@ -60,7 +61,7 @@ second without, and so on; from a larger one it is the other way round. By how m
 multiply them."""
 KEPT, ABOVE = 40, 4
 """States that are kept, of the lowest s and up to `ABOVE` more."""
-GATHERED = 12
+MOST_GATHERED = 12
 """States of the lowest s up to which further ones are looked for."""
 FREE_WORK, MOST_FREE = 1500, 16
 """Free rollouts from a state in each turn, in its elements and in number."""
@@ -161,6 +162,11 @@ class GuardedDescent:
         self.states = sorted([*self.states, state], key=lambda one: one.rank)
         self.states = [one for one in self.states if one.score <= self.score + ABOVE][:KEPT]
 
+    def _begun(self, state: DrawnState, divide: bool) -> tuple[HalfEdgeMesh, Operations]:
+        """The mesh of a state, its strips cut in two if `divide`, and the operations up to it."""
+        mesh = state.mesh(self._mesh)
+        return mesh, state.operations + (divide_chords(mesh) if divide else [])
+
     def _round(
         self, begin: DrawnState, count: int, stop: Callable[[], bool], divide: bool = False
     ) -> list[DrawnState]:
@@ -168,8 +174,7 @@ class GuardedDescent:
 
         Returns the states of lower s, which are noted.
         """
-        mesh = begin.mesh(self._mesh)
-        before = begin.operations + (divide_chords(mesh) if divide else [])
+        mesh, before = self._begun(begin, divide)
         batch = GuardedRollouts(
             mesh, self._policy, self._rng, count, self._max_steps,
             max(self._ceiling, mesh.n_elements), self._stalled,
@@ -191,17 +196,21 @@ class GuardedDescent:
         """A leap from a state, and at the first try guarded rollouts from it as it is and divided,
         until one of them leads on.
         """
-        known, divides = len(self.states), divisible(state.elements)
-        self._leap(state, stop, divides and (state.tries % 2 == 1) == (state.elements < SMALL))
-        for divide in (False, True)[: 1 + divides] if state.tries == 1 else ():
-            if len(self.states) == known and granted(1) > 0 and not stop():
-                self._round(state, 1, stop, divide)
+        divides = divisible(state.elements)
+        divide_first = state.elements < SMALL
+        if self._leap(state, stop, divides and (state.tries % 2 == 1) == divide_first):
+            return
+        if state.tries > 1:
+            return
+        for divide in (False, True) if divides else (False,):
+            if granted(1) <= 0 or stop() or self._round(state, 1, stop, divide):
+                return
 
     def gather(self, stop: Callable[[], bool]) -> None:
         """Look for further states of the lowest s until `stop`, by guarded rollouts from the start
         and by what leads on from states above.
         """
-        while self._start.score > self.score and len(self.lowest) < GATHERED and not stop():
+        while self._start.score > self.score and len(self.lowest) < MOST_GATHERED and not stop():
             self._round(self._start, 1, stop)
             above = [state for state in self.states if state.score > self.score]
             if above and not stop():
@@ -221,23 +230,24 @@ class GuardedDescent:
         state.tries += 1
         return state
 
-    def _leap(self, state: DrawnState, stop: Callable[[], bool], divide: bool) -> None:
-        """Leap from a state, or from what its strips cut in two make of it, to lower s."""
-        mesh = state.mesh(self._mesh)
-        before = state.operations + (divide_chords(mesh) if divide else [])
-        ceiling = max(self._ceiling, int(GROWTH * mesh.n_elements))
-        found = leap(mesh, self._policy, self._rng, stop, ceiling, divide=True)
-        if found is not None:
-            operations, arrays = found
-            self._note(self._thinned(DrawnState.of(before + operations, arrays), stop))
-
-    def _anneal(self, stop: Callable[[], bool]) -> bool:
-        """Anneal from a state, to s* or else to any lower s, and divide what that leads to; returns
-        whether something could be drawn.
+    def _leap(self, state: DrawnState, stop: Callable[[], bool], divide: bool) -> bool:
+        """Leap from a state, or from what its strips cut in two make of it, to lower s; returns
+        whether a leap was found.
         """
+        mesh, before = self._begun(state, divide)
+        ceiling = max(self._ceiling, int(GROWTH * mesh.n_elements))
+        found = leap(mesh, self._policy, self._rng, stop, ceiling)
+        if found is None:
+            return False
+        operations, arrays = found
+        self._note(self._thinned(DrawnState.of(before + operations, arrays), stop))
+        return True
+
+    def _anneal(self, stop: Callable[[], bool]) -> None:
+        """Anneal from a state, to s* or else to any lower s, and divide what that leads to."""
         small = [state for state in self.states if state.elements <= LARGEST_ANNEALED]
         if not small:
-            return False
+            return
         state = self._least_tried(small)
         before = state.mesh(self._mesh)
         for goal in sorted({self._mesh.optimum, state.score - 1}):
@@ -248,8 +258,7 @@ class GuardedDescent:
             )  # fmt: skip
             if drawn is not None:
                 self._note(self._thinned(drawn, stop))
-                return True
-        return False
+                return
 
     def _thinned(self, state: DrawnState, stop: Callable[[], bool]) -> DrawnState:
         """The state thinned out, if it has become larger than the start."""
@@ -277,11 +286,7 @@ class GuardedDescent:
 
         Positions take long: of those whose degrees permit any at most so many are tried.
         """
-        angle = corner_angles(self._mesh)  # no vertex that operations add is a corner
-
-        def usable(mesh: HalfEdgeMesh) -> bool:
-            return bool(layout_bound(mesh.arrays, angle) > THIN_LEAST)
-
+        usable = partial(drawable, angle=corner_angles(self._mesh))
         for after, operations in [pair for pair in reached if usable(pair[0])][:most]:
             if stop():
                 break

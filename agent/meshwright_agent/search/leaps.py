@@ -22,9 +22,9 @@ from meshwright_agent.policy.inference import decide
 from meshwright_agent.policy.policy_files import Policy
 from meshwright_agent.search.annealing import Operations, with_room
 from meshwright_agent.search.coarsening import replayed
-from meshwright_agent.search.divided_layouts import drawn_divided
+from meshwright_agent.search.divided_layouts import drawable, drawn_divided
 from meshwright_core.core.arrays import MeshArrays, copied
-from meshwright_core.geometry.layout_positions import layout_bound, rails_of
+from meshwright_core.geometry.layout_positions import rails_of
 from meshwright_core.geometry.local_positions import local_effort, settle
 from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.mesh import HalfEdgeMesh
@@ -38,8 +38,6 @@ TRIED = 5
 """Leaps that are positioned."""
 DIVIDED = 3
 """Leaps that are divided where none can be drawn as it is."""
-LEAST = 0.1
-"""Sine of the worst corner that the degrees of a leap must permit for it to be divided."""
 RINGS = 3
 """Rings of elements around what has changed whose vertices move too."""
 
@@ -52,13 +50,12 @@ def leap(
     rng: np.random.Generator,
     stop: Callable[[], bool],
     ceiling: int | None = None,
-    divide: bool = False,
 ) -> tuple[Operations, MeshArrays] | None:
     """Operations that lead to lower s, and the arrays there with valid positions; None if no leap
     of this round can be drawn.
 
     mesh: of quads, without inverted elements; not changed. ceiling: largest number of elements, by
-    default that of the policy's task. divide: whether leaps are divided where none can be drawn.
+    default that of the policy's task.
     """
     if ceiling is None:
         ceiling = policy.task.bounds(mesh.n_elements)[1]
@@ -80,11 +77,9 @@ def leap(
         if settle(before, after, rails, local, active) > 0.0:
             return operations, after
         found.append(operations)
-    if not divide:
-        return None
     results = ((operations, replayed(mesh, operations)) for operations in found)
-    drawable = (pair for pair in results if layout_bound(pair[1].arrays, angle) > LEAST)
-    for operations, reached in islice(drawable, DIVIDED):
+    usable = (pair for pair in results if drawable(pair[1], angle))
+    for operations, reached in islice(usable, DIVIDED):
         divisions, drawn = drawn_divided(reached, stop, 1)
         if drawn:
             return operations + divisions, reached.arrays

@@ -25,7 +25,7 @@ from meshwright_agent.search.annealing import anneal
 from meshwright_agent.search.cleanup_removal import without_cleanups
 from meshwright_agent.search.coarsening import coarsen as coarser
 from meshwright_agent.search.coarsening import replayed, undrawable
-from meshwright_agent.search.divided_layouts import FINEST
+from meshwright_agent.search.divided_layouts import FINEST, drawable
 from meshwright_agent.search.drawn_patches import improve_drawn
 from meshwright_agent.search.guarded_coarsening import Coarsener, Layout
 from meshwright_agent.search.guarded_descent import GuardedDescent
@@ -45,7 +45,6 @@ from meshwright_agent.search.solution import Solution, judged
 from meshwright_core.domains.gallery import shape
 from meshwright_core.domains.meshing import benchmark_mesh, mesh_domain
 from meshwright_core.geometry import smoothing
-from meshwright_core.geometry.layout_positions import layout_bound
 from meshwright_core.geometry.quality import inverted, scaled_jacobian
 from meshwright_core.geometry.shape_bound import corner_angles
 from meshwright_core.geometry.turning import has_bends
@@ -482,7 +481,7 @@ def _warm_up(policy: Policy) -> None:
 def _warm_up_curves() -> None:
     """Kick and judge layouts whose sides bend; all else is the same as for straight sides."""
     plate = mesh_domain(shape("plate-with-round-hole"), "quad")
-    layout_bound(plate.arrays, corner_angles(plate))
+    drawable(plate, corner_angles(plate))
     seeker = LayoutSearch(plate, Preference())
     seeker.add([], True, lambda: False)
     seeker.run(lambda: False, 16)
