@@ -328,7 +328,7 @@ def _play(seed: int, events: int) -> dict[str, Any]:
     window = MainWindow(Document(_star("quad"), "star"), ready=True)
     folder = tempfile.TemporaryDirectory()
     window.files.watch(Path(folder.name))
-    window.actions_by_id["quit"].setEnabled(False)  # it is in a menu, too
+    window.actions_by_id["quit"].setVisible(False)  # it is in a menu, too; refresh() enables it
     window.resize(*SIZE)
     window.show()
     window.activateWindow()
