@@ -63,7 +63,7 @@ class KernelPreparation:
 
     @property
     def progress(self) -> tuple[int, int]:
-        """How many parts of the agent's kernels are compiled, and how many there are."""
+        """How many kernels of both stages are compiled, and how many there are."""
         from meshwright_agent.warm_up import progress
 
         return progress()

@@ -4,18 +4,26 @@ import sys
 import threading
 
 import pytest
-from driving import WAIT
+from driving import WAIT, press
+from qtpy.QtCore import Qt
 
 from meshwright.assistant.kernel_preparation import KernelPreparation, Stage
+from meshwright.desktop.application import kernel_warmup
 from meshwright.desktop.application.kernel_warmup import (
-    COMPILING,
     LOADING,
+    UNUSABLE,
     KernelWarmup,
 )
 from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.graphics.theme import theme
+
+
+def waiting(path) -> list[str]:
+    """A command that ends when a file appears."""
+    code = "import os, sys, time\nwhile not os.path.exists(sys.argv[1]): time.sleep(0.01)"
+    return [sys.executable, "-c", code, str(path)]
 
 
 class Prepared:
@@ -32,11 +40,9 @@ class Prepared:
         )
 
     def _prepare(self, load) -> KernelPreparation:
-        return KernelPreparation(lambda stage: stage not in self.cold, load, self._command)
-
-    def _command(self, stage: Stage) -> list[str]:
-        code = "import os, sys, time\nwhile not os.path.exists(sys.argv[1]): time.sleep(0.01)"
-        return [sys.executable, "-c", code, str(self.folder / stage)]
+        return KernelPreparation(
+            lambda stage: stage not in self.cold, load, lambda stage: waiting(self.folder / stage)
+        )
 
     def finish(self, stage: Stage) -> None:
         self.cold.remove(stage)
@@ -59,10 +65,12 @@ def prepared(qtbot, tmp_path):
 def test_each_stage_is_shown_and_enables_what_it_compiled(qtbot, prepared):
     state = prepared([Stage.EDITING, Stage.AGENT])
     state.warmup.start()
-    assert state.status.preparation == COMPILING
+    assert state.status.preparation.startswith("Preparing the operations, once after an update: ")
+    assert state.readiness.preparing == state.status.preparation
+    assert 0 <= state.readiness.share <= 1
     assert not state.readiness.editing
     state.finish(Stage.EDITING)
-    qtbot.waitUntil(lambda: "agent" in state.status.preparation, timeout=WAIT)
+    qtbot.waitUntil(lambda: "search" in state.status.preparation, timeout=WAIT)
     assert state.readiness.editing
     assert not state.readiness.agent
     state.finish(Stage.AGENT)
@@ -116,4 +124,32 @@ def test_a_failure_is_reported_as_a_sentence(qtbot, prepared):
     assert state.notice.text == "The compiled kernels cannot be used: no room"
     qtbot.wait(20)
     assert not state.readiness.editing
-    assert state.status.preparation == ""
+    assert state.status.preparation == state.readiness.preparing == UNUSABLE
+
+
+def test_the_agent_panel_says_what_is_prepared_until_complete_can_be_pressed(
+    qtbot, open_window, star, tmp_path, monkeypatch
+):
+    cold = [Stage.AGENT]
+    monkeypatch.setattr(
+        kernel_warmup,
+        "KernelPreparation",
+        lambda load: KernelPreparation(
+            lambda stage: stage not in cold, load, lambda stage: waiting(tmp_path / "compiled")
+        ),
+    )
+    window = open_window(star, ready=False)
+    panel = window.agent_panel
+    said = panel.progress.text
+    qtbot.waitUntil(lambda: said().startswith("Preparing the search"), timeout=WAIT)
+    assert "once after an update" in said()
+    assert panel.bar.isVisible() and 0 <= panel.bar.share <= 1
+    assert not panel.complete.isEnabled()
+    press(qtbot, window, Qt.Key.Key_Return, Qt.KeyboardModifier.ControlModifier)
+    assert window.status.message == (
+        "Complete: Needs a mesh and a policy that is ready: see the panel Agent."
+    )
+    cold.clear()
+    (tmp_path / "compiled").touch()
+    qtbot.waitUntil(panel.complete.isEnabled, timeout=WAIT)
+    assert said() == "Ready" and not panel.bar.isVisible()

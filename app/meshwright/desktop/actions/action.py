@@ -66,7 +66,7 @@ def has_quads(context: ActionContext) -> bool:
     return context.document.kind == "quad"
 
 
-@needing("Needs a mesh, and the agent must be ready.")
+@needing("Needs a mesh and a policy that is ready: see the panel Agent.")
 def can_run(context: ActionContext) -> bool:
     """The agent could start a run."""
     return has_mesh(context) and context.readiness.agent and bool(context.assistant.policy)

@@ -12,7 +12,7 @@ HINTS = 5
 """Hints that can be applied by a number key."""
 
 
-@needing("Needs a mesh, and the agent must be ready.")
+@needing("Needs a mesh and a policy that is ready: see the panel Agent.")
 def _can_hint(context: ActionContext) -> bool:
     return can_run(context) and context.assistant.state not in (State.SEARCHING, State.GOING)
 

@@ -23,6 +23,7 @@ from meshwright.assistant.outcome import shape_wanted
 from meshwright.assistant.policy_catalogue import kind_of, label, shipped
 from meshwright.assistant.search_runner import PREFERENCES
 from meshwright.desktop.agent.hint_list import HintList
+from meshwright.desktop.application.readiness import Readiness
 from meshwright.desktop.application.settings import Settings
 from meshwright.desktop.controller import Connections
 from meshwright.desktop.widgets import icons
@@ -50,19 +51,22 @@ MOST_FILES = 10
 
 
 class AgentPanel(QWidget):
-    """Shows the state of ``assistant``; its buttons trigger ``actions``."""
+    """Shows the state of ``assistant``, and that of ``readiness`` until policies can run; its
+    buttons trigger ``actions``.
+    """
 
     def __init__(
         self,
         document: Document,
         assistant: Assistant,
+        readiness: Readiness,
         settings: Settings,
         actions: ActionSet,
         theme: Theme,
     ) -> None:
         super().__init__()
         self._document = document
-        self._assistant = assistant
+        self._assistant, self._readiness = assistant, readiness
         self._actions = actions
         self._settings = settings
         self._theme = theme
@@ -76,6 +80,8 @@ class AgentPanel(QWidget):
         self._connections = Connections()
         self._connections.add(document.replaced, self._on_replaced)
         self._connections.add(assistant.changed, self._on_assistant_changed)
+        self._connections.add(readiness.changed, self._on_tick)
+        self._connections.add(readiness.progressed, self._on_tick)
         self._on_replaced()
 
     def release(self) -> None:
@@ -326,10 +332,11 @@ class AgentPanel(QWidget):
         self._on_tick()
 
     def _on_tick(self) -> None:
-        share = self._assistant.progress.share
+        ready = self._readiness.agent
+        share = self._assistant.progress.share if ready else self._readiness.share
         self.bar.setVisible(share is not None)
         self.bar.share = share or 0.0
-        text = activity(self._assistant)
+        text = activity(self._assistant) if ready else self._readiness.preparing
         if text != self.progress.text():
             self.progress.setText(text)
 

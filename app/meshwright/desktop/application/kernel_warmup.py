@@ -1,4 +1,4 @@
-"""Prepares the kernels behind the open window, and shows that in the status bar."""
+"""Prepares the kernels behind the open window, and says how far that is."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from meshwright.desktop.widgets.basic import NoticeBar
 from meshwright.desktop.widgets.status_bar import StatusBar
 from meshwright.graphics.theme import Theme
 
-COMPILING = "Compiling operations (first start only)\u2026"
-LOADING = "Loading operations\u2026"
-COMPILING_AGENT = "Compiling the agent (first start only): {done} of {total}\u2026"
+LOADING = "Loading the operations\u2026"
+COMPILING = "Preparing {what}, once after an update: {done} of {total} parts\u2026"
+COMPILED = {Stage.EDITING: "the operations", Stage.AGENT: "the search"}
+UNUSABLE = "The compiled kernels cannot be used."
 PROGRESS_MILLISECONDS = 1000
 """Milliseconds between updates of the progress."""
 
@@ -29,7 +30,7 @@ def _preparation(load: Callable[[], None]) -> KernelPreparation:
 
 
 class KernelWarmup(Controller):
-    """Updates ``readiness`` as the kernels are compiled and loaded.
+    """Updates ``readiness``, and the status bar, as the kernels are compiled and loaded.
 
     ``prepare(load)`` makes the preparation, ``load()`` loads the kernels in its thread.
     """
@@ -85,24 +86,30 @@ class KernelWarmup(Controller):
         if self._loaded:
             self._readiness.editing = True
             self._readiness.agent = compiling is Stage.READY
-            self._show_progress(compiling is Stage.AGENT)
+            self._show_progress(compiling)
         elif compiling is Stage.EDITING and not self._loading:
-            self._status.show_preparation(COMPILING)
+            self._show_progress(compiling)
         else:
-            self._status.show_preparation(LOADING)
+            self._show(LOADING)
 
-    def _show_progress(self, compiling_agent: bool) -> None:
-        if not compiling_agent:
+    def _show_progress(self, stage: Stage) -> None:
+        """Show how far the compilation is, now and once a second; of READY, that it is over."""
+        if stage is Stage.READY:
             self._progress.stop()
-            self._status.show_preparation("")
+            self._show("")
             return
         done, total = self._preparation.progress
-        self._status.show_preparation(COMPILING_AGENT.format(done=done, total=total))
+        self._show(COMPILING.format(what=COMPILED[stage], done=done, total=total), done / total)
         if not self._progress.isActive():
             self._progress.start()
 
+    def _show(self, text: str, share: float | None = None) -> None:
+        self._status.show_preparation(text)
+        self._readiness.show_progress(text, share)
+
     def _fail(self, sentence: str) -> None:
         self._failed = True
+        self._progress.stop()
         if not self._closed:
-            self._status.show_preparation("")
+            self._show(UNUSABLE)
             self._notice.show_message(sentence)

@@ -8,11 +8,32 @@ PREPARING = "The operations are still being compiled. Please wait a moment."
 
 
 class Readiness:
-    """``editing``: operations can be applied; ``agent``: policies can run. ``changed()``."""
+    """``editing``: operations can be applied; ``agent``: policies can run. ``changed()`` when one
+    of the two has changed, ``progressed()`` when :attr:`preparing` or :attr:`share` has.
+    """
 
     def __init__(self, editing: bool = False, agent: bool = False) -> None:
         self.changed = Signal()
+        self.progressed = Signal()
         self._editing, self._agent = editing, agent
+        self._preparing = ""
+        self._share: float | None = None
+
+    @property
+    def preparing(self) -> str:
+        """What is being compiled or loaded, as a sentence; empty if nothing is."""
+        return self._preparing
+
+    @property
+    def share(self) -> float | None:
+        """How much of it is done, 0 to 1; None if nothing is being done or it is not known."""
+        return self._share
+
+    def show_progress(self, preparing: str, share: float | None = None) -> None:
+        """Set :attr:`preparing` and :attr:`share`."""
+        if (preparing, share) != (self._preparing, self._share):
+            self._preparing, self._share = preparing, share
+            self.progressed.emit()
 
     @property
     def editing(self) -> bool:

@@ -156,7 +156,7 @@ class MainWindow(QMainWindow):
         self.spoken = SpokenHalfedge(document, canvas, self.hover, colours)
         self.unused_keys = UnusedKeys(document, canvas, actions, status, colours)
         self.errors = ErrorNotice(document, notice, colours)
-        self.agent_panel = AgentPanel(document, assistant, settings, actions, colours)
+        self.agent_panel = AgentPanel(document, assistant, readiness, settings, actions, colours)
         self.hints = HintsController(
             document, assistant, canvas, self.agent_panel, status, notice, colours
         )
