@@ -11,6 +11,7 @@ from meshwright.assistant.kernel_preparation import KernelPreparation, Stage
 from meshwright.desktop.application import kernel_warmup
 from meshwright.desktop.application.kernel_warmup import (
     LOADING,
+    MINUTES,
     UNUSABLE,
     KernelWarmup,
 )
@@ -66,7 +67,7 @@ def test_each_stage_is_shown_and_enables_what_it_compiled(qtbot, prepared):
     state = prepared([Stage.EDITING, Stage.AGENT])
     state.warmup.start()
     assert state.status.preparation.startswith("Preparing the operations, once after an update: ")
-    assert state.readiness.preparing == state.status.preparation
+    assert state.readiness.preparing == f"{state.status.preparation} {MINUTES}"
     assert 0 <= state.readiness.share <= 1
     assert not state.readiness.editing
     state.finish(Stage.EDITING)
@@ -142,7 +143,7 @@ def test_the_agent_panel_says_what_is_prepared_until_complete_can_be_pressed(
     panel = window.agent_panel
     said = panel.progress.text
     qtbot.waitUntil(lambda: said().startswith("Preparing the search"), timeout=WAIT)
-    assert "once after an update" in said()
+    assert "once after an update" in said() and MINUTES in said()
     assert panel.bar.isVisible() and 0 <= panel.bar.share <= 1
     assert not panel.complete.isEnabled()
     press(qtbot, window, Qt.Key.Key_Return, Qt.KeyboardModifier.ControlModifier)
@@ -153,3 +154,5 @@ def test_the_agent_panel_says_what_is_prepared_until_complete_can_be_pressed(
     (tmp_path / "compiled").touch()
     qtbot.waitUntil(panel.complete.isEnabled, timeout=WAIT)
     assert said() == "Ready" and not panel.bar.isVisible()
+    qtbot.mouseClick(panel.complete, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: window.document.history.cursor > 0, timeout=WAIT)

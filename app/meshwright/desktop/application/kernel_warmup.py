@@ -17,6 +17,8 @@ from meshwright.graphics.theme import Theme
 
 LOADING = "Loading the operations\u2026"
 COMPILING = "Preparing {what}, once after an update: {done} of {total} parts\u2026"
+MINUTES = "One to four minutes in all."
+"""How long compilation takes on two cores, said where there is room."""
 COMPILED = {Stage.EDITING: "the operations", Stage.AGENT: "the search"}
 UNUSABLE = "The compiled kernels cannot be used."
 PROGRESS_MILLISECONDS = 1000
@@ -99,13 +101,14 @@ class KernelWarmup(Controller):
             self._show("")
             return
         done, total = self._preparation.progress
-        self._show(COMPILING.format(what=COMPILED[stage], done=done, total=total), done / total)
+        text = COMPILING.format(what=COMPILED[stage], done=done, total=total)
+        self._show(text, done / total, MINUTES)
         if not self._progress.isActive():
             self._progress.start()
 
-    def _show(self, text: str, share: float | None = None) -> None:
+    def _show(self, text: str, share: float | None = None, more: str = "") -> None:
         self._status.show_preparation(text)
-        self._readiness.show_progress(text, share)
+        self._readiness.show_progress(f"{text} {more}".rstrip(), share)
 
     def _fail(self, sentence: str) -> None:
         self._failed = True
