@@ -34,11 +34,13 @@ SIZE_SECONDS = 10.0
 """Time of *Complete* where the elements keep their size."""
 PATIENCE = 2
 """Rounds without success after which *Complete* ends."""
-MANY_BLOCKS = 30
-"""Blocks beyond which *Complete* does not end with its first, short round."""
+MANY_BLOCKS = 20
+"""Quads beyond which *Complete* does not end with its first, short round."""
 NOTHING_BETTER = "nothing better was found in {:.0f} s"
 PREFERENCES = ("blocks", "balanced", "shape")
 """What counts at s*: few blocks, a good worst corner, or both."""
+_SPREAD = 4
+"""Where the sum of squares stands in the rank of a solution."""
 NEAR = 1e-3
 """How far below the aim a shape may be and still count as reached."""
 
@@ -183,7 +185,7 @@ class SearchRunner:
         while True:
             found = self._round(start, seconds, done)
             done += found.rollouts
-            won = best is None or found.rank[:-1] < best.rank[:-1]
+            won = best is None or _is_better(found, best)
             if won:
                 operations = before + list(found.operations)
                 best, self.target = found, start.copy()
@@ -199,7 +201,12 @@ class SearchRunner:
                 break
             if self._is_done(self.target) and not self._deserves_more(best):
                 break
-            if best.perfect and lost:  # others of the same s are found from the start
+            few = self._fewer(best, seconds, done)
+            if few is not None:
+                done += few.rollouts
+                start, before = self._mesh.copy(), list(few.operations)
+                few.carry_out(start)
+            elif best.perfect and lost:  # others of the same s are found from the start
                 start, before = self._mesh, []
             else:
                 start, before = self.target, operations
@@ -232,9 +239,25 @@ class SearchRunner:
         """
         assert self.target is not None
         uneven = best.aims.spread and largest_delta(self.target) > 1
-        searched = best.coarse and self.shape is not None
-        many = searched and self.target.n_elements > MANY_BLOCKS
-        return self._rounds == 1 and (uneven or many)
+        return self._rounds == 1 and (uneven or self._has_many(best))
+
+    def _has_many(self, best: Solution) -> bool:
+        """Whether s* is reached with many blocks."""
+        assert self.target is not None
+        searched = best.coarse and self.shape is not None and self.target.score == best.optimum
+        return searched and self.target.n_elements > MANY_BLOCKS
+
+    def _fewer(self, best: Solution, seconds: float, done: int) -> Solution | None:
+        """After the first round, where it has left many blocks: a solution with less than half of
+        them and any shape; None if there is none.
+
+        Many blocks of one layout lie in spirals, which a search does not undo. It soon finds a good
+        shape from few blocks of a bad one.
+        """
+        if self._rounds > 1 or self._effort.prefer != "balanced" or not self._has_many(best):
+            return None
+        few = self._round(self._mesh, seconds, done, "blocks")
+        return few if few.perfect and 2 * few.elements < best.elements else None
 
     def _note_end(self, lost: int) -> None:
         """Say why a search in rounds has ended, where it was not stopped and more is wanted."""
@@ -261,7 +284,9 @@ class SearchRunner:
         self.shape = ShapeGoal.of(found.mesh, effort)
         return list(found.operations)
 
-    def _round(self, start: HalfEdgeMesh, seconds: float | None, done: int) -> Solution:
+    def _round(
+        self, start: HalfEdgeMesh, seconds: float | None, done: int, prefer: str = ""
+    ) -> Solution:
         from meshwright_agent.search.solver import solve
 
         self._rounds += 1
@@ -273,7 +298,7 @@ class SearchRunner:
             seed=self._seed + 1009 * self._rounds,
             workers=_workers(),
             coarsen=self._effort.coarsen,
-            prefer=self._effort.prefer,
+            prefer=prefer or self._effort.prefer,
             progress=lambda rollouts, best: self._progress(done + rollouts, best),
             cancelled=self._enough.is_set,
         )
@@ -294,6 +319,17 @@ class SearchRunner:
         if found.score == found.optimum:
             self.reason = "nothing lower is possible by changing this region alone"
         return list(found.operations)
+
+
+def _is_better(found: Solution, best: Solution) -> bool:
+    """Whether a solution is better: by its rank, except that half as many blocks, where there
+    are many, count more than how evenly the irregularity is spread.
+    """
+    few, many = sorted((found.elements, best.elements))
+    alike = found.coarse and best.coarse and found.rank[:_SPREAD] == best.rank[:_SPREAD]
+    if alike and many > MANY_BLOCKS and many >= 2 * few:
+        return found.elements == few
+    return found.rank[:-1] < best.rank[:-1]
 
 
 def _workers() -> int:

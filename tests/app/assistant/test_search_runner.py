@@ -155,19 +155,80 @@ def test_complete_looks_once_more_where_a_vertex_is_irregular_by_two(
     assert len(asked) == count
 
 
-@pytest.mark.parametrize(("most", "count"), [(9, 1), (8, 2)])
-def test_complete_looks_once_more_where_many_blocks_are_left(dented, monkeypatch, most, count):
-    asked = []
+@pytest.mark.parametrize(
+    ("most", "prefer", "asked"),
+    [
+        (9, "balanced", [(3.0, "")]),
+        (8, "balanced", [(3.0, ""), (3.0, "blocks"), (24.0, "")]),
+        (8, "shape", [(3.0, ""), (24.0, "")]),
+    ],
+)
+def test_complete_looks_once_more_where_many_blocks_are_left(
+    dented, monkeypatch, most, prefer, asked
+):
+    rounds = []
 
-    def one(self, start, seconds, done):
+    def one(self, start, seconds, done, prefer=""):
         self._rounds += 1
-        asked.append(seconds)
+        rounds.append((seconds, prefer))
         return judged(Solution([], 0, start.optimum, 0, aims=Preference().aims(1.0, 1.0)), start)
 
     monkeypatch.setattr(SearchRunner, "_round", one)
     monkeypatch.setattr(search_runner, "MANY_BLOCKS", most)
-    SearchRunner(dented, None, 0, Effort(until_done=True), Event(), lambda *a: None).step()
-    assert len(asked) == count
+    effort = Effort(until_done=True, prefer=prefer)
+    SearchRunner(dented, None, 0, effort, Event(), lambda *a: None).step()
+    assert rounds == asked
+
+
+def test_complete_goes_on_from_few_blocks_where_many_are_left(dented, monkeypatch):
+    """The second round starts with the result of a search for few blocks, and its operations lead
+    from the mesh that was given to the end of that round.
+    """
+    monkeypatch.setattr(search_runner, "MANY_BLOCKS", 8)
+    mesh, starts = dented, []
+    given = mesh.copy()
+
+    def without_lines(start, times):
+        """A solution that removes lines of the grid, one after the other."""
+        here, operations = start.copy(), []
+        for _ in range(times):
+            halfedge = next(h for h in range(4 * start.n_elements) if _removable(here, h))
+            here.apply("cleanup", halfedge)
+            operations.append(("cleanup", halfedge))
+        aims = Preference().aims(1.0, 1.0)
+        return judged(Solution(operations, 0, start.optimum, 0, aims=aims, coarse=True), start)
+
+    def one(self, start, seconds, done, prefer=""):
+        self._rounds += 1
+        starts.append(start.n_elements)
+        return without_lines(start, (0, 2, 1)[len(starts) - 1])
+
+    monkeypatch.setattr(SearchRunner, "_round", one)
+    runner = SearchRunner(mesh, None, 0, Effort(until_done=True), Event(), lambda *a: None)
+    for operation, halfedge in runner.step():
+        given.apply(operation, halfedge)
+    assert starts == [9, 9, 3]
+    assert given.n_elements == runner.target.n_elements == 2
+
+
+def _removable(mesh, halfedge):
+    return mesh.live(halfedge) and bool(mesh.check("cleanup", halfedge))
+
+
+def test_half_of_many_blocks_count_more_than_an_even_spread():
+    aims = Preference().aims(1.0, 1.0)
+
+    def found(elements, sum_delta2, worst=0.7):
+        return Solution(
+            [], 0, 12, 12, sum_delta2=sum_delta2, elements=elements, coarse=True, aims=aims,
+            worst_scaled_jacobian=worst, worst_shape=1.0,
+        )  # fmt: skip
+
+    better = search_runner._is_better
+    assert better(found(11, 14), found(60, 12)) and not better(found(60, 12), found(11, 14))
+    assert better(found(40, 12), found(60, 14)) and not better(found(40, 14), found(60, 12))
+    assert better(found(18, 12), found(9, 14)) and not better(found(9, 14), found(18, 12))
+    assert not better(found(11, 14, worst=0.2), found(60, 12))
 
 
 def test_long_thin_elements_are_not_the_wanted_shape():
